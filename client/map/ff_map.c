@@ -3,8 +3,7 @@
 #include "../../protocol/ff_assert.h"
 #include "../../protocol/ff_terrain.h"
 
-#define DOWN        (-16384) /* a pitch */
-#define AWAY_WU_MAX ((int64_t)1 << 30)
+#define DOWN (-16384) /* a pitch */
 /* drawn nodes have so many pixels for a triangle, at least */
 #define PIXELS_OF_A_TRIANGLE 10
 
@@ -20,10 +19,11 @@ ff_map ff_map_make(const int32_t place_wu[3], int32_t yaw, int64_t px_wu_q8, con
 {
     FF_ASSERT(px_wu_q8 > 0 && lens->focal_q8 >= 256);
     int64_t focal_q8 = within((int64_t)lens->focal_q8 * FF_MAP_LENS, 256, INT32_MAX);
-    return (ff_map){ .place_wu = { place_wu[0], place_wu[1], place_wu[2] },
-                     .yaw = yaw,
-                     .away_wu = within(c3d_muldiv64(px_wu_q8, focal_q8, 65536), 1, AWAY_WU_MAX),
-                     .focal_q8 = (int32_t)focal_q8 };
+    return (
+        ff_map){ .place_wu = { place_wu[0], place_wu[1], place_wu[2] },
+                 .yaw = yaw,
+                 .away_wu = within(c3d_muldiv64(px_wu_q8, focal_q8, 65536), 1, FF_MAP_AWAY_WU_MAX),
+                 .focal_q8 = (int32_t)focal_q8 };
 }
 
 /* Where the eye looks from straight down: unit vector, Q30. */
@@ -47,7 +47,7 @@ ff_map ff_map_of_camera(const c3d_camera *camera, int64_t away_wu)
     int32_t forward[3];
     ff_map map = { .yaw = camera->yaw,
                    .tilt = camera->pitch - DOWN,
-                   .away_wu = within(away_wu, 1, AWAY_WU_MAX),
+                   .away_wu = within(away_wu, 1, FF_MAP_AWAY_WU_MAX),
                    .focal_q8 = camera->focal_q8 };
     forward_q30(camera->yaw, camera->pitch, forward);
     for (int axis = 0; axis < 3; axis++) map.place_wu[axis] = camera->pos_wu[axis];
@@ -58,7 +58,7 @@ ff_map ff_map_of_camera(const c3d_camera *camera, int64_t away_wu)
 void ff_map_camera(const ff_map *map, c3d_camera *camera)
 {
     int32_t forward[3];
-    FF_ASSERT(map->away_wu >= 1 && map->away_wu <= AWAY_WU_MAX);
+    FF_ASSERT(map->away_wu >= 1 && map->away_wu <= FF_MAP_AWAY_WU_MAX);
     camera->yaw = map->yaw;
     camera->pitch = map->tilt + DOWN;
     camera->roll = 0;

@@ -10,13 +10,15 @@
 
 /* How many times as far away, and as long a lens, as the flight's at the same scale. */
 #define FF_MAP_LENS 4
+/* How far away the eye may be: of wide windows at large scales that is what ends a zoom. */
+#define FF_MAP_AWAY_WU_MAX ((int64_t)1 << 30)
 
 /* A view of a place, from above or aslant: any camera without roll is one. */
 typedef struct ff_map {
     int32_t place_wu[3]; /* on the ground, in the middle of the picture; axes as the camera's */
     int32_t yaw;         /* brad16, clockwise from north: what is up in the picture */
     int32_t tilt;        /* brad16 from straight down; 16384: level */
-    int64_t away_wu;     /* of the eye from the place, 1 to 2^30 */
+    int64_t away_wu;     /* of the eye from the place, 1 to FF_MAP_AWAY_WU_MAX */
     int32_t focal_q8;    /* of its lens, as c3d_camera's */
 } ff_map;
 

@@ -55,9 +55,10 @@ void view_map_toggle(view_map *map, const view_fly *fly, const ff_client *client
 
 static void zoom(view_map *map, int64_t times_q16)
 {
-    int64_t focal_q8 = map->map.focal_q8;
+    int64_t focal_q8 = map->map.focal_q8, most_wu = PX_WU_Q8_MAX * focal_q8 >> 16;
     map->map.away_wu = within(c3d_muldiv64(map->map.away_wu, times_q16, 65536),
-                              PX_WU_Q8_MIN * focal_q8 >> 16, PX_WU_Q8_MAX * focal_q8 >> 16);
+                              PX_WU_Q8_MIN * focal_q8 >> 16,
+                              most_wu < FF_MAP_AWAY_WU_MAX ? most_wu : FF_MAP_AWAY_WU_MAX);
 }
 
 static void pan(view_map *map, int64_t right_wu, int64_t up_wu)

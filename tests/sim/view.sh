@@ -297,6 +297,15 @@ done
 "$view" "$pack" --headless --backend soft --place 3840,2000,400 --no-hud --map --script <(printf '0 settle\n1 screenshot %s\n' "$work/first.png") >"$work/said" 2>"$work/error"
 read -r _ first < <(pictures differences "$work/map.png" "$work/first.png")
 [ "${first:--1}" -ge 0 ] && [ "$first" -lt 500 ]; result $? "begins with the map: $first"
+{
+    echo 0 settle
+    for ((i = 0; i < 100; i++)); do echo 1 scroll down; done
+    echo 2 settle
+    for ((i = 0; i < 200; i++)); do echo 3 scroll up; done
+    echo 4 settle
+} >"$work/zoom.txt"
+timeout 60 "$view" "$pack" --headless --backend soft --map --script "$work/zoom.txt" >"$work/said" 2>"$work/error" && [ ! -s "$work/error" ]
+result $? "a map as small and as large as can be" || cat "$work/error"
 
 # ---- wrong words ----
 python3 tests/rig/hills.py 65 "$work/far.raw" &&
