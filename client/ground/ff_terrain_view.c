@@ -272,6 +272,7 @@ static void draw_contours(ff_terrain_view *view, const ff_terrain_info *info, co
     uint8_t strip[5];
     unsigned strips = ff_strips_for(drawn->coarser, strip);
     ff_tree_vertices(view->tree, drawn, 0, view->vertices);
+    ff_tree_clear_hidden(view->tree, drawn, view->vertices);
     ff_ground_frame_vertices(&view->frame, info, drawn, view->vertices, view->heights_per_node);
     for (unsigned i = 0; i < strips; i++)
         ff_contours_strip(&view->contours, &node, view->index + view->first[strip[i]],

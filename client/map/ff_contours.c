@@ -113,6 +113,13 @@ static void sort(corner corners[3])
     FF_ASSERT(corners[1].height_wu <= corners[2].height_wu);
 }
 
+/* 1 when all of a triangle lies under another ground. */
+static int is_hidden(const ff_contour_node *node, const uint16_t index[3])
+{
+    return !(node->vertices[index[0]].rgba[3] | node->vertices[index[1]].rgba[3] |
+             node->vertices[index[2]].rgba[3]);
+}
+
 static int32_t floor_divide(int32_t n, int32_t d)
 {
     FF_ASSERT(d > 0);
@@ -151,11 +158,13 @@ void ff_contours_strip(ff_contours *contours, const ff_contour_node *node, const
 {
     int inside = 0; /* so many of the last vertices lie in the band */
     FF_ASSERT(contours->vertex != NULL && contours->interval_wu > 0);
+    contours->band_wu = 0; /* that of the strip before may be of another interval */
     for (uint32_t i = 0; i < count; i++) {
         int64_t above_wu = ff_height_wu(node->info, node->heights[index[i]]) - contours->band_wu;
         inside = above_wu >= 0 && above_wu < contours->interval_wu ? inside + 1 : 0;
         const uint16_t *t = index + i - 2;
         if (i < 2 || inside >= 3 || t[0] == t[1] || t[1] == t[2] || t[0] == t[2]) continue;
+        if (is_hidden(node, t)) continue;
         int64_t band_wu = contours->band_wu;
         add_triangle(contours, node, t);
         if (contours->band_wu != band_wu) inside = 0;

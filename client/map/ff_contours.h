@@ -19,14 +19,14 @@ typedef struct ff_contours {
     c3d_strip lines;
     int32_t interval_wu; /* between them; 0: none */
     uint32_t count;      /* of vertices that wait */
-    int64_t band_wu;     /* a height that lines have: of those last met the one below */
+    int64_t band_wu;     /* in a strip, a height that lines have: of those last met the one below */
 } ff_contours;
 
 /* A node as it was drawn. */
 typedef struct ff_contour_node {
     const ff_terrain_info *info;
     const uint16_t *heights;    /* of the terrain */
-    const c3d_vertex *vertices; /* in the frame of `ground` */
+    const c3d_vertex *vertices; /* in the frame of `ground`; alpha 0: another ground lies over it */
     const c3d_draw *ground;     /* the call that drew it */
 } ff_contour_node;
 
@@ -35,7 +35,7 @@ extern const int ff_contours_built;
 /* Makes the lines on the device. FF_OK or FF_ERR_MEMORY. */
 int ff_contours_make(ff_contours *contours, c3d_device *device, c3d_vertex *vertex);
 /* Draws what lines pass over a triangle strip of the node; at most FF_CONTOURS_OF_ONE over each
- * triangle, and none over one that more would pass. */
+ * triangle, and none over one that more would pass, nor over one under another ground. */
 #define FF_CONTOURS_OF_ONE 8
 void ff_contours_strip(ff_contours *contours, const ff_contour_node *node, const uint16_t *index,
                        uint32_t count);

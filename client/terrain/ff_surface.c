@@ -109,6 +109,33 @@ void ff_tree_vertices(const ff_tree *tree, const ff_drawn *drawn, int shaded, c3
     }
 }
 
+/* 1 where a ground stands that is drawn over one after it; as wide as a triangle reaches. */
+static int is_under(const ff_tree *tree, uint32_t ground, const int32_t place_wu[3])
+{
+    const ff_cover *cover = tree->cover;
+    for (uint32_t rank = 0; rank < cover->rank[ground]; rank++) {
+        const ff_area *area = &cover->stands[cover->ranked[rank]];
+        if (place_wu[0] >= area->lo[0] && place_wu[0] <= area->hi[0] &&
+            place_wu[1] >= area->lo[1] && place_wu[1] <= area->hi[1])
+            return 1;
+    }
+    return 0;
+}
+
+void ff_tree_clear_hidden(const ff_tree *tree, const ff_drawn *drawn, c3d_vertex *vertices)
+{
+    const ff_terrain_info *info = ff_ground_of(tree, drawn->key);
+    uint32_t side = ff_node_side(info), ground = (uint32_t)(info - tree->ground);
+    int32_t place_wu[3];
+    FF_ASSERT(drawn->node != NULL && ground < tree->ground_count);
+    if (!tree->cover || !tree->cover->rank[ground]) return;
+    for (uint32_t i = 0; i < side * side; i++) {
+        ff_shape_place(info, drawn->key, &drawn->node->placed, i % side, i / side,
+                       drawn->heights[i], place_wu);
+        if (is_under(tree, ground, place_wu)) vertices[i].rgba[3] = 0;
+    }
+}
+
 /* A point in a node's grid, Q16 cells from its south-west corner. */
 typedef struct grid_point {
     int64_t x, y;

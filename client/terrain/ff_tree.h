@@ -225,6 +225,9 @@ uint32_t ff_tree_reserve(const ff_tree *tree, ff_wish *list, uint32_t capacity);
  * of its ground. */
 void ff_tree_vertices(const ff_tree *tree, const ff_drawn *drawn, int shaded, c3d_vertex *out);
 
+/* Takes the alpha (0) of those vertices over which another ground is drawn. */
+void ff_tree_clear_hidden(const ff_tree *tree, const ff_drawn *drawn, c3d_vertex *vertices);
+
 /* How many steps lower each of the node's vertices is drawn than its height says, for the seam with
  * another ground; NULL: none is, or nobody knows, for the node is out of view. */
 const uint16_t *ff_tree_drop(const ff_tree *tree, const ff_drawn *drawn);

@@ -119,19 +119,27 @@ static uint32_t *picture(client_rig *rig, int32_t contour_wu)
     return copy;
 }
 
-static void open_map(client_rig *rig)
+/* Of the pack the rig has, and of `more`. */
+static void begin_map(client_rig *rig, const ff_source_desc *more)
 {
-    rig_open(rig, 0);
     rig->desc.backend = c3d_backend_soft();
     rig->desc.surface_api = sys_surface_memory();
     rig->desc.frame_format = C3D_RGBA8888;
     rig->desc.use_map = 1;
     rig->desc.use_plain_arrays = 1;
+    rig->desc.more = more;
+    rig->desc.more_count = more != NULL;
     rig_local_client(rig, 4 * MB);
     const int32_t place[3] = { 2000 * METRE, 2000 * METRE, 0 };
     ff_map map = ff_map_make(place, 0, 10 * METRE << 8, &lens);
     ff_map_camera(&map, &rig->camera);
     assert_true(rig_settle(rig, 600));
+}
+
+static void open_map(client_rig *rig)
+{
+    rig_open(rig, 0);
+    begin_map(rig, NULL);
 }
 
 /* The heights that pixels show; INT32_MAX: no ground. */
@@ -202,6 +210,74 @@ static void contours_lie_where_the_ground_has_their_height(void **state)
     rig_close(&rig);
 }
 
+/* Whatever a strip before, or a picture, had them lie apart. */
+static void contours_are_those_of_their_interval(void **state)
+{
+    (void)state;
+    client_rig rig;
+    open_map(&rig);
+    for (int32_t interval_wu = 30 * METRE; interval_wu < 300 * METRE; interval_wu += 7 * METRE) {
+        uint32_t *first = picture(&rig, interval_wu);
+        for (int32_t before_wu = 4 * METRE; before_wu <= 50 * METRE; before_wu *= 2) {
+            free(picture(&rig, before_wu));
+            uint32_t *again = picture(&rig, interval_wu);
+            assert_memory_equal(again, first, WIDTH * HEIGHT * sizeof *first);
+            free(again);
+        }
+        free(first);
+    }
+    rig_close(&rig);
+}
+
+/* The hills by every eighth sample: ground that reaches 2 km further to all sides. */
+static uint16_t coarse_hills(void *context, uint32_t x, uint32_t y)
+{
+    return pack_fixture_hills(context, 8 * x, 8 * y);
+}
+
+static uint8_t *open_coarse(ff_pack *pack)
+{
+    pack_fixture_desc desc = { .info = pack_fixture_info(5, 1, 1), .height = coarse_hills };
+    size_t bytes;
+    desc.info.spacing_wu *= 8;
+    desc.info.epsg = 32632;
+    desc.info.origin_x_mm = 498000 * 1000;
+    desc.info.origin_y_mm = 4998000 * INT64_C(1000);
+    uint8_t *made = pack_fixture_make(&desc, &bytes);
+    assert_int_equal(ff_pack_open(pack, made, bytes), FF_OK);
+    return made;
+}
+
+static void ground_under_another_has_no_contours(void **state)
+{
+    (void)state;
+    client_rig rig;
+    ff_pack coarse;
+    uint8_t *bytes = open_coarse(&coarse);
+    const ff_source_desc more = { .pack = &coarse };
+    unsigned wrong = 0, lines = 0;
+    rig_open(&rig, 0);
+    rig_use_place(&rig, 32632, 500000, 5000000);
+    begin_map(&rig, &more);
+    assert_int_equal(ff_client_source_state(rig.client, 1), FF_OK);
+    uint32_t *without = picture(&rig, 0);
+    int32_t *height_wu = heights(&rig);
+    uint32_t *with = picture(&rig, 50 * METRE);
+    for (int y = 1; y < HEIGHT - 1; y++)
+        for (int x = 1; x < WIDTH - 1; x++) {
+            int changed = with[y * WIDTH + x] != without[y * WIDTH + x];
+            lines += changed;
+            wrong += changed && !may_be(height_wu, x, y, 50 * METRE);
+        }
+    assert_true(lines > 1000);
+    assert_true(wrong * 100 <= lines);
+    free(without);
+    free(with);
+    free(height_wu);
+    rig_close(&rig);
+    free(bytes);
+}
+
 static void the_viewer_is_a_point(void **state)
 {
     (void)state;
@@ -254,6 +330,8 @@ int main(void)
         cmocka_unit_test(the_way_to_a_flight_has_no_jump),
         cmocka_unit_test(contours_and_bars_are_round),
         cmocka_unit_test(contours_lie_where_the_ground_has_their_height),
+        cmocka_unit_test(contours_are_those_of_their_interval),
+        cmocka_unit_test(ground_under_another_has_no_contours),
         cmocka_unit_test(the_viewer_is_a_point),
         cmocka_unit_test(who_has_no_map_pays_nothing),
     };
