@@ -173,7 +173,7 @@ typedef struct ff_client_desc {
     ff_balance_desc balance;
     uint8_t use_thread;       /* 1: ff_client_create starts a thread that calls ff_client_work */
     uint8_t use_plain_arrays; /* 1: no vertex buffers */
-    uint8_t use_map;          /* 1: room for what ff_client_set_map draws, 3 KB */
+    uint8_t use_map;          /* 1: room for what ff_client_set_map draws, some 5 KB */
     /* 1: cameras given before a terrain is known are places on it already, as of a device that
      * knows which ground it is on: what they show is asked for with the greeting, a round trip
      * earlier */

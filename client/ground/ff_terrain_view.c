@@ -271,6 +271,7 @@ static void draw_contours(ff_terrain_view *view, const ff_terrain_info *info, co
     const ff_contour_node node = { info, drawn->heights, view->vertices, ground };
     uint8_t strip[5];
     unsigned strips = ff_strips_for(drawn->coarser, strip);
+    FF_ASSERT(strips >= 1 && strips <= sizeof strip);
     ff_tree_vertices(view->tree, drawn, 0, view->vertices);
     ff_tree_clear_hidden(view->tree, drawn, view->vertices);
     ff_ground_frame_vertices(&view->frame, info, drawn, view->vertices, view->heights_per_node);

@@ -133,8 +133,10 @@ static void add_triangle(ff_contours *contours, const ff_contour_node *node,
     corner c[3] = { corner_of(node, index[0]), corner_of(node, index[1]),
                     corner_of(node, index[2]) };
     sort(c);
+    FF_ASSERT(c[0].height_wu <= c[1].height_wu && c[1].height_wu <= c[2].height_wu);
     int32_t first = floor_divide(c[0].height_wu, contours->interval_wu) + 1,
             last = floor_divide(c[2].height_wu, contours->interval_wu);
+    FF_ASSERT(first - 1 <= last);
     contours->band_wu = (int64_t)(first - 1) * contours->interval_wu;
     FF_ASSERT(first <= last + 1);
     if (last - first >= FF_CONTOURS_OF_ONE) return;
