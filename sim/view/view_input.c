@@ -169,7 +169,10 @@ static void press(view_app *app, int code)
     switch (code) {
         case 'p': next_far(app); break;
         case 'i': next_layer(app); break;
-        case 'n': view_map_toggle(&app->map, &app->fly, app->client, 1); break;
+        case 'n':
+            app->fly.dragging = 0; /* a finger that is down moves neither any more */
+            view_map_toggle(&app->map, &app->fly, app->client, 1);
+            break;
         case 'c': app->map.contours = !app->map.contours; break;
         case 'l':
             if (app->link) view_link_cycle(app->link);
@@ -231,6 +234,7 @@ void view_handle(view_app *app, const sys_event *event)
                 app->blit.window_height = event->u.resize.height;
             } else {
                 view_fly_resize(&app->fly, event->u.resize.width, event->u.resize.height);
+                if (app->map_quality) view_set_quality(app); /* its triangles go by the window */
             }
             app->redraw = 1;
             break;

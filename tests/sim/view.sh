@@ -307,6 +307,21 @@ read -r _ first < <(pictures differences "$work/map.png" "$work/first.png")
 timeout 60 "$view" "$pack" --headless --backend soft --map --script "$work/zoom.txt" >"$work/said" 2>"$work/error" && [ ! -s "$work/error" ]
 result $? "a map as small and as large as can be" || cat "$work/error"
 
+cat >"$work/finger.txt" <<END
+0 settle
+0 screenshot $work/before.png
+1 touch down 100 100
+2 key n
+3 touch up 100 100
+40 key n
+80 touch move 30 100
+81 settle
+82 screenshot $work/after.png
+END
+"$view" "$pack" --headless --backend soft --place 3840,2000,400 --no-hud --script "$work/finger.txt" >"$work/said" 2>"$work/error"
+read -r _ after < <(pictures differences "$work"/{before,after}.png)
+[ "${after:-99999}" -lt 500 ]; result $? "a finger down as the map comes turns no flight after it: $after"
+
 # ---- wrong words ----
 python3 tests/rig/hills.py 65 "$work/far.raw" &&
     python3 tests/rig/placed.py "$work/far.raw" 65 0,0,65,65 1 30 32632 "$work/far.vrt" &&
