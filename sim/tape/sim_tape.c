@@ -29,8 +29,9 @@ static int play_send(void *state, const uint8_t *bytes, size_t count)
         return FF_ERR_CLOSED;
     }
     int32_t sent = take_i32(player);
-    player->differs = (uint32_t)take(player, 4) != sim_tape_hash(bytes, count);
-    return sent;
+    player->differs = (uint32_t)take(player, 4) != sim_tape_hash(bytes, count) ||
+                      (sent > 0 && (uint32_t)sent > count);
+    return player->differs ? FF_ERR_CLOSED : sent;
 }
 
 static int play_recv(void *state, uint8_t *bytes, size_t capacity)

@@ -103,6 +103,11 @@ result $? "chosen where there was none"
 flies taped both --layer autumn --event 4:layer= --event 6:layer=off --backend soft565 --tape "$work/tape"
 "$bin/farfield-handheld" --tape "$work/tape" >"$work/played.log" 2>"$work/played.err"
 result $? "a tape plays a flight in which layers are chosen"
+# its head says "no views", which the client that was recorded asked for
+printf '\1' | dd of="$work/tape" bs=1 seek=$((8 + 4 * 19)) conv=notrunc 2>"$work/dd.err"
+"$bin/farfield-handheld" --tape "$work/tape" --no-pictures >"$work/played.log" 2>"$work/played.err"
+[ $? = 1 ] && grep -q "does something else than the one recorded" "$work/played.err"
+result $? "one of another client is told"
 flies unknown both --layer winter
 [ $? != 0 ] && tail -1 "$work/unknown.err" | grep -q "no layer of this name; it has: one without a name autumn"
 result $? "an unknown one is refused, with those that there are"
