@@ -47,6 +47,7 @@ void ff_contours_point(ff_contours *contours, const int64_t offset_wu[3])
                        .point_px = PLACE_PX,
                        .xy_scale_wu = 1,
                        .z_scale_q16 = 1u << 16 };
+    FF_ASSERT(contours->count == 0);
     for (int axis = 0; axis < 3; axis++) point.origin_wu[axis] = offset_wu[axis];
     point.mesh = c3d_mesh_make(contours->device, &here, 1);
     if (!point.mesh.id) return;
@@ -126,6 +127,14 @@ static int32_t floor_divide(int32_t n, int32_t d)
     return n / d - (n % d < 0);
 }
 
+/* 1 when the middle corner lies left of the way from the lowest to the highest one. */
+static int is_left(const corner c[3])
+{
+    int64_t up_x = c[2].place_wu[0] - c[0].place_wu[0], up_y = c[2].place_wu[1] - c[0].place_wu[1],
+            x = c[1].place_wu[0] - c[0].place_wu[0], y = c[1].place_wu[1] - c[0].place_wu[1];
+    return up_x * y > up_y * x;
+}
+
 /* Lines whose height is above the lowest corner's, and not above the highest one's. */
 static void add_triangle(ff_contours *contours, const ff_contour_node *node,
                          const uint16_t index[3])
@@ -137,18 +146,21 @@ static void add_triangle(ff_contours *contours, const ff_contour_node *node,
     int32_t first = floor_divide(c[0].height_wu, contours->interval_wu) + 1,
             last = floor_divide(c[2].height_wu, contours->interval_wu);
     FF_ASSERT(first - 1 <= last);
+    /* each begins where another ends, higher ground to its right: a GL leaves out a line's last
+     * pixel */
+    int left = is_left(c);
     contours->band_wu = (int64_t)(first - 1) * contours->interval_wu;
     FF_ASSERT(first <= last + 1);
     if (last - first >= FF_CONTOURS_OF_ONE) return;
     for (int32_t number = first; number <= last; number++) {
         int64_t level_wu = (int64_t)number * contours->interval_wu;
         if (contours->count == FF_CONTOUR_INDICES) ff_contours_flush(contours, node->ground);
-        c3d_vertex *line = contours->vertex + contours->count;
-        pass(&c[0], &c[2], level_wu, &line[0]);
+        c3d_vertex *line = contours->vertex + contours->count, *end = line + left;
+        pass(&c[0], &c[2], level_wu, line + !left);
         if (level_wu > c[1].height_wu)
-            pass(&c[1], &c[2], level_wu, &line[1]);
+            pass(&c[1], &c[2], level_wu, end);
         else
-            pass(&c[0], &c[1], level_wu, &line[1]);
+            pass(&c[0], &c[1], level_wu, end);
         colour(&line[0], number);
         colour(&line[1], number);
         contours->count += 2;

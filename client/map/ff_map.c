@@ -106,6 +106,7 @@ ff_map ff_map_between(const ff_map *from, const ff_map *to, uint32_t part_q16)
                    .focal_q8 = (int32_t)by_ratio(from->focal_q8, to->focal_q8, part_q16) };
     for (int axis = 0; axis < 3; axis++)
         map.place_wu[axis] = straight(from->place_wu[axis], to->place_wu[axis], part_q16);
+    FF_ASSERT(map.away_wu >= 1 && map.focal_q8 >= 1);
     return map;
 }
 
