@@ -245,12 +245,14 @@ static void run(ff_client *client, server servers[2], input *in)
                           .focal_q8 = 208 * 256 };
     while (in->at < in->end) {
         unsigned step = next(in), amount = step >> 4;
+        int32_t *axis_wu = &camera.pos_wu[step >> 3 & 1];
         server *s = &servers[step >> 3 & 1];
         switch (step & 7) {
             case 0: welcome(s, in, (amount & 3) + 1); break;
             case 1: now_us += (int64_t)amount * amount * 100000; break;
             case 2:
-                camera.pos_wu[step >> 3 & 1] += (int32_t)((next(in) - 128u) << (amount + 4));
+                /* after many such steps round to the other end */
+                *axis_wu = (int32_t)((uint32_t)*axis_wu + ((next(in) - 128u) << (amount + 4)));
                 camera.yaw += (int32_t)amount << 12;
                 break;
             case 3: answer(s, amount, 1); break;
