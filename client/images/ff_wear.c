@@ -121,7 +121,7 @@ static void choose(chooser *c)
             depth++;
             continue;
         }
-        FF_ASSERT(c->count < FF_WEAR_MAX);
+        FF_ASSERT(c->count < FF_WEAR_MAX || !path[depth].squares);
         if (path[depth].squares)
             c->list[c->count++] = (ff_wear){ path[depth].image, path[depth].squares };
         depth--;

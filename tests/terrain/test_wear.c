@@ -135,11 +135,32 @@ static void texels_are_as_large_as_pixels(void **state)
     assert_true(parts > nodes + 100);
 }
 
+static void a_node_wears_as_many_images_as_it_has_room_for(void **state)
+{
+    (void)state;
+    client_rig rig;
+    rig_open(&rig, 5);
+    rig_use_node_log2(&rig, FF_NODE_LOG2_MAX, 5);
+    rig_local_client(&rig, 8 * MB);
+    assert_true(rig_settle(&rig, 600));
+    const ff_tree *tree = ff_client_tree(rig.client);
+    const ff_drawn *drawn;
+    assert_true(ff_tree_drawn(tree, &drawn) > 0);
+    /* the rig's pack has no images so fine */
+    ff_terrain_info *info = (ff_terrain_info *)(uintptr_t)ff_tree_ground(tree, drawn->key);
+    info->texture_levels = (uint8_t)(ff_key_level(drawn->key) + FF_IMAGE_DEPTH_MAX + 1);
+    ff_texel_look look = { .focal_q8 = rig.camera.focal_q8, .texel_px_q8 = 1, .across = 1 };
+    memcpy(look.pos_wu, rig.camera.pos_wu, sizeof look.pos_wu);
+    assert_int_equal(check_node(tree, drawn, &look), FF_WEAR_MAX);
+    rig_close(&rig);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(images_below_a_node_share_its_squares_out),
         cmocka_unit_test(texels_are_as_large_as_pixels),
+        cmocka_unit_test(a_node_wears_as_many_images_as_it_has_room_for),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
