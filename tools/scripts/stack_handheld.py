@@ -38,7 +38,7 @@ THROUGH_POINTERS = [
     (r"ff_pool\.c:|^ff_tree_resha(de_beside|de|pe)$", r"ff_terrain_view\.c:on_evict$"),
     (r"ff_sets_draw\.c:|^ff_sets_make_fins$", None),  # those who watch fins: checks
     (r"^ff_held_pictures_get$", r"ff_textures\.c:find_coded$"),
-    (r"^ff_terrain_view_draw$|ff_terrain_view\.c:", r"^ff_sets_lay$"),
+    (r"^ff_node_draw$|ff_node_draw\.c:", r"^ff_sets_lay$"),
     (r"^ff_box_in_view$", r"ff_view_cull\.c:(narrow_)?beyond_plane$"),
     (r"ff_stream\.c:|^ff_stream_", r"posix/tcp\.c:tcp_|sim_tape\.c:play_"),
     (r"^inflate|^updatewindow$", r"ff_inflate\.c:arena_"),
