@@ -350,7 +350,9 @@ int ff_client_set_map(ff_client *client, const ff_map_show *map)
 {
     if (!client->desc.use_map || !client->desc.backend) return FF_ERR_UNSUPPORTED;
     if (map->contour_wu && map->contour_wu < FF_CONTOUR_WU_MIN) return FF_ERR_ARGUMENT;
-    client->dirty |= memcmp(&client->map, map, sizeof *map) != 0;
+    client->dirty |= client->map.contour_wu != map->contour_wu ||
+                     client->map.has_place != map->has_place ||
+                     memcmp(client->map.place_wu, map->place_wu, sizeof map->place_wu) != 0;
     client->map = *map;
     return FF_OK;
 }

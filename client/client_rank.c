@@ -177,10 +177,6 @@ int ff_client_rank(ff_client *client, const ff_view *view, const ff_quality *qua
     for (unsigned i = 0; i < client->source_count; i++) {
         ff_source *source = ff_client_source(client, i);
         if (source->io) ff_stream_hurry(&source->stream, a.turns);
-        if (source->io)
-            ff_stream_allow(&source->stream, client->desc.balance.mode == FF_BALANCE_ON
-                                                 ? client->desc.balance.link_bytes_s
-                                                 : 0);
         ff_requests_rank_begin(&source->requests);
     }
     if (!ff_client_own_ground(client))

@@ -30,6 +30,17 @@ void ff_source_make(ff_client *client, unsigned number, const ff_source_room *ro
                    desc->answer_timeout_ms, room->recv, room->recv_bytes);
     source->stream.reach_wu = ff_client_reach_wu(client);
     if (room->about) ff_stream_want_about(&source->stream, desc->about, room->about);
+    ff_client_allow(client, source);
+}
+
+void ff_client_allow(const ff_client *client, ff_source *source)
+{
+    const ff_balance_desc *balance = &client->desc.balance;
+    unsigned links = ff_budget_links(&client->desc);
+    if (!source->io) return;
+    FF_ASSERT(links > 0);
+    uint32_t bytes_s = balance->mode == FF_BALANCE_ON ? balance->link_bytes_s / links : 0;
+    ff_stream_allow(&source->stream, bytes_s);
 }
 
 void ff_client_take_pack(const ff_client *client, ff_source *source)

@@ -101,6 +101,8 @@ typedef struct ff_source_room {
  * have the same ground, and then each hands out all levels of it, so that keys mean the same. */
 int32_t ff_client_reach_wu(const ff_client *client);
 void ff_source_make(ff_client *client, unsigned number, const ff_source_room *room);
+/* Tells a source's worker its share of the balance's budget of bytes: as much as any other link. */
+void ff_client_allow(const ff_client *client, ff_source *source);
 int ff_client_step_source(ff_client *client, ff_source *source, int64_t now_us);
 /* Who it is, as the embedder says. */
 static inline ff_source_desc ff_client_source_desc(const ff_client *client, unsigned number)

@@ -96,6 +96,8 @@ void ff_client_set_balance(ff_client *client, const ff_balance_desc *desc)
 {
     int fresh = client->desc.balance.mode == FF_BALANCE_OFF;
     client->desc.balance = *desc;
+    for (unsigned i = 0; i < client->source_count; i++)
+        ff_client_allow(client, ff_client_source(client, i));
     if (client->have_terrain && desc->mode == FF_BALANCE_OFF) {
         client->panorama.desc.back_plane_wu = client->desc.panorama.back_plane_wu;
         client->panorama.desc.error_px_q8 = client->desc.panorama.error_px_q8;

@@ -135,23 +135,21 @@ static int is_left(const corner c[3])
     return up_x * y > up_y * x;
 }
 
-/* Lines whose height is above the lowest corner's, and not above the highest one's. */
-static void add_triangle(ff_contours *contours, const ff_contour_node *node,
-                         const uint16_t index[3])
+/* Lines whose height is above the lowest corner's, and not above the highest one's. Returns the
+ * height of the line below the lowest corner. */
+static int64_t add_triangle(ff_contours *contours, const ff_contour_node *node,
+                            const uint16_t index[3])
 {
     corner c[3] = { corner_of(node, index[0]), corner_of(node, index[1]),
                     corner_of(node, index[2]) };
     sort(c);
-    FF_ASSERT(c[0].height_wu <= c[1].height_wu && c[1].height_wu <= c[2].height_wu);
     int32_t first = floor_divide(c[0].height_wu, contours->interval_wu) + 1,
             last = floor_divide(c[2].height_wu, contours->interval_wu);
-    FF_ASSERT(first - 1 <= last);
+    FF_ASSERT(first <= last + 1);
     /* each begins where another ends, higher ground to its right: a GL leaves out a line's last
      * pixel */
     int left = is_left(c);
-    contours->band_wu = (int64_t)(first - 1) * contours->interval_wu;
-    FF_ASSERT(first <= last + 1);
-    if (last - first >= FF_CONTOURS_OF_ONE) return;
+    if (last - first >= FF_CONTOURS_OF_ONE) last = first - 1;
     for (int32_t number = first; number <= last; number++) {
         int64_t level_wu = (int64_t)number * contours->interval_wu;
         if (contours->count == FF_CONTOUR_INDICES) ff_contours_flush(contours, node->ground);
@@ -165,22 +163,23 @@ static void add_triangle(ff_contours *contours, const ff_contour_node *node,
         colour(&line[1], number);
         contours->count += 2;
     }
+    return (int64_t)(first - 1) * contours->interval_wu;
 }
 
 void ff_contours_strip(ff_contours *contours, const ff_contour_node *node, const uint16_t *index,
                        uint32_t count)
 {
-    int inside = 0; /* so many of the last vertices lie in the band */
+    int64_t band_wu = 0; /* a height that lines have: of those last met the one below */
+    int inside = 0;      /* so many of the last vertices lie between it and the next */
     FF_ASSERT(contours->vertex != NULL && contours->interval_wu > 0);
-    contours->band_wu = 0; /* that of the strip before may be of another interval */
     for (uint32_t i = 0; i < count; i++) {
-        int64_t above_wu = ff_height_wu(node->info, node->heights[index[i]]) - contours->band_wu;
+        int64_t above_wu = ff_height_wu(node->info, node->heights[index[i]]) - band_wu;
         inside = above_wu >= 0 && above_wu < contours->interval_wu ? inside + 1 : 0;
+        if (i < 2 || inside >= 3) continue;
         const uint16_t *t = index + i - 2;
-        if (i < 2 || inside >= 3 || t[0] == t[1] || t[1] == t[2] || t[0] == t[2]) continue;
-        if (is_hidden(node, t)) continue;
-        int64_t band_wu = contours->band_wu;
-        add_triangle(contours, node, t);
-        if (contours->band_wu != band_wu) inside = 0;
+        if (t[0] == t[1] || t[1] == t[2] || t[0] == t[2] || is_hidden(node, t)) continue;
+        int64_t below_wu = add_triangle(contours, node, t);
+        if (below_wu != band_wu) inside = 0;
+        band_wu = below_wu;
     }
 }

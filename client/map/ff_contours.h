@@ -19,7 +19,6 @@ typedef struct ff_contours {
     c3d_strip lines;
     int32_t interval_wu; /* between them; 0: none */
     uint32_t count;      /* of vertices that wait */
-    int64_t band_wu;     /* in a strip, a height that lines have: of those last met the one below */
 } ff_contours;
 
 /* A node as it was drawn. */

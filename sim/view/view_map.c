@@ -128,7 +128,6 @@ void view_map_tell(view_map *map, const view_fly *fly, ff_client *client)
 {
     ff_map_show show = { .has_place = map->part_q16 < 65536 };
     int32_t ground_wu = 0;
-    memset(show.place_wu, 0, sizeof show.place_wu);
     if (show.has_place || map->contours) show.contour_wu = ff_map_contour_wu(map->px_wu_q8);
     if (show.has_place) {
         (void)above_ground(fly, client, &ground_wu);

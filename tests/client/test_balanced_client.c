@@ -201,6 +201,26 @@ static void no_nearest_back_plane_is_too_far(void **state)
     rig_close(&rig);
 }
 
+/* A budget of bytes counts from when it is set: what came before is not owed. */
+static void a_budget_of_bytes_begins_when_it_is_set(void **state)
+{
+    (void)state;
+    client_rig rig;
+    open_balanced(&rig, FF_BALANCE_OFF, 0);
+    rig.desc.panorama.enabled = 0;
+    ff_client_set_panorama(rig.client, &rig.desc.panorama);
+    assert_true(rig_settle(&rig, 600));
+    uint64_t before = rig.bytes_down;
+    rig.desc.balance = (ff_balance_desc){ .mode = FF_BALANCE_ON, .link_bytes_s = 200 };
+    ff_client_set_balance(rig.client, &rig.desc.balance);
+    rig.camera.pos_wu[0] = 3000 * METRE;
+    rig.camera.yaw += 32768;
+    for (int i = 0; i < 10 * 20; i++) rig_step(&rig, STEP_US);
+    assert_true(before > (10 + 4) * 200); /* else it could be paid meanwhile */
+    assert_in_range(rig.bytes_down - before, 10 * 200 / 4, (10 + 4 + 2) * 200);
+    rig_close(&rig);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(a_client_keeps_a_budget_of_triangles),
@@ -208,6 +228,7 @@ int main(void)
                                         cmocka_unit_test(the_ends_and_off),
                                         cmocka_unit_test(the_back_plane_waits_for_its_panorama),
                                         cmocka_unit_test(the_panorama_waits_for_the_ground),
-                                        cmocka_unit_test(no_nearest_back_plane_is_too_far) };
+                                        cmocka_unit_test(no_nearest_back_plane_is_too_far),
+                                        cmocka_unit_test(a_budget_of_bytes_begins_when_it_is_set) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

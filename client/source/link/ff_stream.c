@@ -295,7 +295,12 @@ static int in_company(ff_stream *stream, int64_t now_us)
 static uint32_t purse(ff_stream *stream, uint32_t bytes_s, int64_t now_us)
 {
     int64_t most = (int64_t)bytes_s * PURSE_S, passed_us = now_us - stream->purse_us;
-    if (!bytes_s) return UINT32_MAX;
+    if (!bytes_s) { /* a budget that is set later begins anew */
+        stream->purse = 0;
+        stream->purse_us = INT64_MIN / 2;
+        stream->purse_down = stream->bytes_down;
+        return UINT32_MAX;
+    }
     FF_ASSERT(stream->bytes_down >= stream->purse_down);
     if (passed_us > PURSE_S * 1000000ll) passed_us = PURSE_S * 1000000ll;
     stream->purse += passed_us * bytes_s -
